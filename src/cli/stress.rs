@@ -23,11 +23,10 @@ use super::{CliError, Exit, Terminal};
 
 /// Find the inputs for which a function fails numerically
 ///
-/// With a shader, examines one of its functions: the inputs with the largest errors of float32, beside double
-/// precision; whether the inputs or the formula are the reason; the operation that loses the digits; NaN and
-/// infinities; and properties. The ranges of the inputs are those that the shader passes to the function. For
-/// a function that intersects a ray with a sphere, 160-bit arithmetic is the reference, and common mistakes
-/// are recognized.
+/// With a shader, examines one of its functions: the inputs with the largest errors of float32, beside 160-bit
+/// arithmetic; whether the inputs or the formula are the reason; the operation that loses the digits; NaN and
+/// infinities; and properties. The ranges of the inputs are those that the shader passes to the function. In a
+/// function that intersects a ray with a sphere, common mistakes are recognized.
 ///
 /// Without one, tests formulas for ray–sphere and ray–quadric intersection, and for the start of rays that
 /// leave a surface, with extreme inputs. Prints where each formula fails in f32; with -v also in f64.

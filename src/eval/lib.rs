@@ -52,6 +52,7 @@
 //!   formulas agree far below what is visible.
 //! - [`RandomRounding`] perturbs every f64 operation by a random unit in the last place (Monte Carlo
 //!   arithmetic). A pixel whose color changes by it is ill-conditioned.
+//! - [`Wide`] has 160 bits, and takes thousands of times as long: it says how wrong f64 is.
 //!
 //! # Undefined behavior
 //!
@@ -105,6 +106,7 @@ pub use exec::observe::{MESA_CAP, Observations, Observed};
 pub use exec::places::Places;
 pub use exec::recorder::{ExecutionTrace, ForcedPrefix, TraceEvent, TraceFault, TraceValue};
 pub use exec::settings::{Engine, Settings};
+pub use exec::wide::Wide;
 pub use ir::{Call, CallId, Event, EventId, EventKind, Fault, Site, Store, StoreId, TraceSchema};
 pub use ir::{Origin, Part, PartId, PartKind};
 pub use parametric::{ParametricProgram, Point, PointEvaluator};

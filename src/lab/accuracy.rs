@@ -7,7 +7,7 @@ use crate::chart::{self, HeatMap, Panel};
 use crate::csv_table;
 use crate::stress::errors;
 
-const COLUMNS: [&str; 15] = [
+const COLUMNS: [&str; 16] = [
     "function",
     "output",
     "case",
@@ -19,9 +19,10 @@ const COLUMNS: [&str; 15] = [
     "absolute_error",
     "inherent_error_ulp",
     "excess",
-    "reference_error_ulp",
+    "double_error_ulp",
+    "reference_bits",
     "f32",
-    "f64",
+    "reference",
     "call",
 ];
 
@@ -53,12 +54,13 @@ fn cells(report: &Report, output: &OutputErrors, kind: &str, worst: &WorstCase) 
         number(output.p99),
         output.not_finite.to_string(),
         number(worst.ulps),
-        number((worst.single - worst.double).abs()),
+        number((worst.single - worst.reference).abs()),
         number(worst.inherent_ulps),
         number(worst.excess),
-        number(worst.reference_ulps),
+        number(worst.double_ulps),
+        worst.reference_bits.to_string(),
         format!("{:e}", worst.single as f32),
-        format!("{:e}", worst.double),
+        format!("{:e}", worst.reference),
         spreadsheet_text(&worst.call),
     ]
 }

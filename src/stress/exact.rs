@@ -1,151 +1,38 @@
-//! The exact reference: ray–quadric intersection in integer arithmetic.
+//! The exact reference: ray–quadric intersection without rounding.
 //!
 //! Each f32 is an integer times a power of two, and so are sums and products of them. Whether a ray hits a
-//! surface is the sign of such a number, computed without rounding; roots are then computed to more bits than
-//! any tested type has.
+//! surface is the sign of such a number; roots are then computed to more bits than any tested type has.
 
-use std::cmp::Ordering;
-use std::ops::{Add, Mul, Neg, Sub};
+use dashu_float::round::mode::Zero;
+use dashu_float::{Context, FBig};
 
-use dashu_int::IBig;
-use dashu_int::ops::{Abs, BitTest, SquareRoot};
+/// A number that is computed without rounding: its precision is unlimited.
+type Exact = FBig<Zero, 2>;
 
-/// The precision of roots and quotients, in bits: three times that of f64, so that the remainder is far below
-/// its last place.
-const BITS: usize = 160;
+/// The context of roots and quotients, which are truncated to three times the bits of f64, so that the
+/// remainder is far below its last place.
+const TRUNCATED: Context<Zero> = Context::new(160);
 
-/// The number mantissa · 2^exponent.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Dyadic {
-    mantissa: IBig,
-    exponent: isize,
+/// Converts a float; `None` if it is infinite or NaN.
+fn exact(value: f32) -> Option<Exact> {
+    let number = Exact::try_from(value).ok()?;
+    value.is_finite().then(|| unlimited(number))
 }
 
-impl Dyadic {
-    /// Converts a float; `None` if it is infinite or NaN.
-    fn new(value: f32) -> Option<Self> {
-        if !value.is_finite() {
-            return None;
-        }
-        let bits = value.to_bits();
-        let (field, fraction) = ((bits >> 23) & 0xff, bits & 0x7f_ffff);
-        // A denormal has the exponent of the smallest normal number, and no leading 1.
-        let (mantissa, exponent) = match field {
-            0 => (fraction, 1),
-            _ => (fraction | 0x80_0000, field),
-        };
-        let mantissa = IBig::from(mantissa);
-        Some(Self {
-            mantissa: if value.is_sign_negative() {
-                -mantissa
-            } else {
-                mantissa
-            },
-            exponent: exponent as isize - 150,
-        })
-    }
-
-    fn sign(&self) -> Ordering {
-        self.mantissa.cmp(&IBig::ZERO)
-    }
-
-    /// Both mantissas at the smaller exponent.
-    fn aligned(&self, other: &Self) -> (IBig, IBig, isize) {
-        let exponent = self.exponent.min(other.exponent);
-        let shifted = |one: &Self| &one.mantissa << (one.exponent - exponent) as usize;
-        (shifted(self), shifted(other), exponent)
-    }
-
-    fn bits(&self) -> usize {
-        (&self.mantissa).abs().bit_len()
-    }
-
-    /// The square root of a non-negative number, rounded down to at least [`BITS`] bits.
-    fn sqrt(&self) -> Self {
-        let mut shift = (2 * BITS).saturating_sub(self.bits()) as isize;
-        // Half of the exponent must be an integer.
-        shift += (self.exponent - shift).rem_euclid(2);
-        let radicand = (&self.mantissa).abs() << shift as usize;
-        Self {
-            mantissa: IBig::from(radicand.sqrt()),
-            exponent: (self.exponent - shift) / 2,
-        }
-    }
-
-    /// The quotient by a nonzero number, truncated to at least [`BITS`] bits.
-    fn over(&self, other: &Self) -> Self {
-        let shift = (BITS + other.bits()).saturating_sub(self.bits());
-        Self {
-            mantissa: (&self.mantissa << shift) / &other.mantissa,
-            exponent: self.exponent - other.exponent - shift as isize,
-        }
-    }
-
-    fn cmp(&self, other: &Self) -> Ordering {
-        let (one, other, _) = self.aligned(other);
-        one.cmp(&other)
-    }
-
-    /// The number truncated to f64, and the remainder likewise.
-    fn pair(&self) -> DoubleDouble {
-        let high = self.leading();
-        let rest = self - &high.0;
-        DoubleDouble {
-            high: high.1,
-            low: rest.leading().1,
-        }
-    }
-
-    /// The leading 53 bits, and their value.
-    fn leading(&self) -> (Self, f64) {
-        let drop = self.bits().saturating_sub(53);
-        let cut = (&self.mantissa).abs() >> drop;
-        let negative = self.sign() == Ordering::Less;
-        let exponent = self.exponent + drop as isize;
-        // It has at most 53 bits: the conversion is exact.
-        let size = u64::try_from(&cut).unwrap_or(u64::MAX) as f64;
-        let value = libm::scalbn(size, exponent as i32);
-        let (mantissa, value) = if negative { (-cut, -value) } else { (cut, value) };
-        (Self { mantissa, exponent }, value)
-    }
+fn unlimited(number: Exact) -> Exact {
+    number.with_precision(0).value()
 }
 
-macro_rules! operation {
-    ($trait:ident, $method:ident, $a:ident, $b:ident => $value:expr) => {
-        impl $trait for &Dyadic {
-            type Output = Dyadic;
-
-            fn $method(self, other: Self) -> Dyadic {
-                let ($a, $b) = (self, other);
-                $value
-            }
-        }
-    };
+/// The quotient by a nonzero number.
+fn quotient(dividend: &Exact, divisor: &Exact) -> Exact {
+    let quotient = TRUNCATED.div(dividend.repr(), divisor.repr());
+    unlimited(TRUNCATED.unwrap_fp(quotient))
 }
 
-impl Neg for Dyadic {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self {
-            mantissa: -self.mantissa,
-            ..self
-        }
-    }
+/// The square root of a number that is not negative.
+fn root(number: &Exact) -> Exact {
+    unlimited(TRUNCATED.unwrap_fp(TRUNCATED.sqrt(number.repr())))
 }
-
-operation!(Add, add, a, b => {
-    let (a, b, exponent) = a.aligned(b);
-    Dyadic { mantissa: a + b, exponent }
-});
-operation!(Sub, sub, a, b => {
-    let (a, b, exponent) = a.aligned(b);
-    Dyadic { mantissa: a - b, exponent }
-});
-operation!(Mul, mul, a, b => Dyadic {
-    mantissa: &a.mantissa * &b.mantissa,
-    exponent: a.exponent + b.exponent,
-});
 
 /// A number of about a hundred bits: the sum of two f64.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -157,6 +44,16 @@ pub struct DoubleDouble {
 }
 
 impl DoubleDouble {
+    fn new(number: &Exact) -> Self {
+        let high = number.to_f64().value();
+        // Finite numbers of this size are f64.
+        let rest = Exact::try_from(high).map_or(Exact::ZERO, |high| number - unlimited(high));
+        Self {
+            high,
+            low: rest.to_f64().value(),
+        }
+    }
+
     /// The error of `value`, in units in the last place of a number of `digits` binary digits at this
     /// magnitude.
     #[must_use]
@@ -180,78 +77,73 @@ pub struct Intersection {
 }
 
 /// Solves a t² − 2 b t + c = 0.
-fn solve(a: &Dyadic, b: &Dyadic, c: &Dyadic, disc: &Dyadic) -> Vec<Dyadic> {
-    let zero = |number: &Dyadic| number.sign() == Ordering::Equal;
-    if disc.sign() == Ordering::Less || (zero(a) && zero(b)) {
+fn solve(a: &Exact, b: &Exact, c: &Exact, disc: &Exact) -> Vec<Exact> {
+    let zero = Exact::ZERO;
+    if *disc < zero || (*a == zero && *b == zero) {
         return Vec::new();
     }
-    if zero(a) {
-        return vec![c.over(&(b + b))];
+    if *a == zero {
+        return vec![quotient(c, &(b + b))];
     }
-    let root = disc.sqrt();
-    let q = if b.sign() == Ordering::Less {
-        b - &root
-    } else {
-        b + &root
-    };
-    if zero(&q) {
+    let root = root(disc);
+    let q = if *b < zero { b - root } else { b + root };
+    if q == zero {
         return vec![q.clone(), q];
     }
-    let mut roots = vec![c.over(&q), q.over(a)];
-    roots.sort_by(Dyadic::cmp);
+    let mut roots = vec![quotient(c, &q), quotient(&q, a)];
+    roots.sort();
     roots
 }
 
 /// `unit` normalizes the discriminant.
-fn intersect(a: &Dyadic, b: &Dyadic, c: &Dyadic, unit: &Dyadic) -> Intersection {
-    let disc = &(b * b) - &(a * c);
+fn intersect(a: &Exact, b: &Exact, c: &Exact, unit: &Exact) -> Intersection {
+    let disc = b * b - a * c;
     let roots = solve(a, b, c, &disc);
-    let ahead = roots.iter().find(|t| t.sign() == Ordering::Greater);
+    let ahead = roots.iter().find(|&t| *t > Exact::ZERO);
     Intersection {
-        t: ahead.map(Dyadic::pair),
-        roots: roots.iter().map(Dyadic::pair).collect(),
-        discriminant: if unit.sign() == Ordering::Equal {
+        t: ahead.map(DoubleDouble::new),
+        roots: roots.iter().map(DoubleDouble::new).collect(),
+        discriminant: if *unit == Exact::ZERO {
             0.0
         } else {
-            disc.over(unit).pair().high
+            quotient(&disc, unit).to_f64().value()
         },
     }
 }
 
-fn vector(v: [f32; 3]) -> Option<[Dyadic; 3]> {
-    let [x, y, z] = v.map(Dyadic::new);
+fn vector(v: [f32; 3]) -> Option<[Exact; 3]> {
+    let [x, y, z] = v.map(exact);
     Some([x?, y?, z?])
 }
 
-fn dot(u: &[Dyadic; 3], v: &[Dyadic; 3]) -> Dyadic {
-    &(&(&u[0] * &v[0]) + &(&u[1] * &v[1])) + &(&u[2] * &v[2])
+fn dot(u: &[Exact; 3], v: &[Exact; 3]) -> Exact {
+    &u[0] * &v[0] + &u[1] * &v[1] + &u[2] * &v[2]
 }
 
 /// Intersects the ray from o along d, of any length, with the sphere of center c and radius r; `None` if a
 /// part is infinite or NaN.
 #[must_use]
 pub fn sphere(o: [f32; 3], d: [f32; 3], c: [f32; 3], r: f32) -> Option<Intersection> {
-    let (o, d, c, r) = (vector(o)?, vector(d)?, vector(c)?, Dyadic::new(r)?);
+    let (o, d, c, r) = (vector(o)?, vector(d)?, vector(c)?, exact(r)?);
     let f = [0, 1, 2].map(|i| &o[i] - &c[i]);
     let toward = [0, 1, 2].map(|i| &c[i] - &o[i]);
     let r2 = &r * &r;
     let a = dot(&d, &d);
     let unit = &a * &r2;
-    Some(intersect(&a, &dot(&toward, &d), &(&dot(&f, &f) - &r2), &unit))
+    Some(intersect(&a, &dot(&toward, &d), &(dot(&f, &f) - r2), &unit))
 }
 
 /// Intersects it with the quadric q·p² + 2 g z + k = 0, where p² is taken by component.
 #[must_use]
 pub fn quadric(o: [f32; 3], d: [f32; 3], q: [f32; 3], g: f32, k: f32) -> Option<Intersection> {
     let (o, d, q) = (vector(o)?, vector(d)?, vector(q)?);
-    let (g, k) = (Dyadic::new(g)?, Dyadic::new(k)?);
-    let weighted = |u: &[Dyadic; 3], v: &[Dyadic; 3]| dot(&[0, 1, 2].map(|i| &q[i] * &u[i]), v);
-    let half = &weighted(&d, &o) + &(&g * &d[2]);
-    let b = -half;
+    let (g, k) = (exact(g)?, exact(k)?);
+    let weighted = |u: &[Exact; 3], v: &[Exact; 3]| dot(&[0, 1, 2].map(|i| &q[i] * &u[i]), v);
+    let b = -(weighted(&d, &o) + &g * &d[2]);
     let gz = &g * &o[2];
-    let c = &(&weighted(&o, &o) + &(&gz + &gz)) + &k;
+    let c = weighted(&o, &o) + &gz + &gz + k;
     let a = weighted(&d, &d);
-    let unit = &dot(&d, &d) * &dot(&q, &q);
+    let unit = dot(&d, &d) * dot(&q, &q);
     Some(intersect(&a, &b, &c, &unit))
 }
 

@@ -69,19 +69,20 @@ impl ShaderRunner {
     ///
     /// If the evaluator fails, or the time is up.
     pub fn colors<N: Number>(&self, frame: &Frame) -> Result<Vec<[f64; 3]>, RunError> {
-        self.colors_with::<N>(frame, N::Noise::default())
+        self.colors_with::<N>(frame, N::Noise::default(), self.deadline)
     }
 
-    /// The same with a seed of random rounding, which other number types ignore.
+    /// The same with a seed of random rounding, which other number types ignore, and another deadline.
     pub(crate) fn colors_with<N: Number>(
         &self,
         frame: &Frame,
         noise: N::Noise,
+        deadline: Option<Instant>,
     ) -> Result<Vec<[f64; 3]>, RunError> {
         let settings = eval::Settings::<N> {
             undefined: UndefinedPolicy::Plain,
             noise,
-            deadline: self.deadline,
+            deadline,
             ..eval::Settings::default()
         };
         let framebuffer = self.program.render(frame, &settings)?.framebuffer;

@@ -16,6 +16,7 @@ use crate::exec::places::Part;
 use crate::exec::recorder::{ExecutionTrace, ForcedPrefix};
 use crate::exec::settings::Settings;
 use crate::exec::tile::FrameJob;
+use crate::exec::wide::Wide;
 use crate::lower::LoweredCode;
 
 /// Where a part of a frame is rendered to.
@@ -44,7 +45,7 @@ macro_rules! numbers {
     };
 }
 numbers! {
-    f32, f64, RandomRounding;
+    f32, f64, RandomRounding, Wide;
 
     /// Selects the instructions for a frame.
     #[doc(hidden)]

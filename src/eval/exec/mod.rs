@@ -17,3 +17,4 @@ pub(crate) mod recorder;
 pub(crate) mod settings;
 pub(crate) mod texture;
 pub(crate) mod tile;
+pub(crate) mod wide;

@@ -2,9 +2,9 @@
 //! texture of floats.
 
 use std::fmt::Write as _;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use toyproof_eval::{Number, RandomRounding, Seed};
+use toyproof_eval::{Failure, Number, RandomRounding, Seed, Wide};
 use toyproof_glsl::tree::Scalar;
 use toyproof_glsl::{self as glsl, ADDED_MAIN, Checked, Dialect};
 use toyproof_image::{Frame, Image, Texture};
@@ -69,10 +69,21 @@ impl<'a> Evaluator<'a> {
         cases: &[Case],
         noise: N::Noise,
     ) -> Result<Vec<Outputs>, RunError> {
+        self.evaluate_by::<N>(cases, noise, self.shader.deadline)
+    }
+
+    fn evaluate_by<N: Number>(
+        &self,
+        cases: &[Case],
+        noise: N::Noise,
+        deadline: Option<Instant>,
+    ) -> Result<Vec<Outputs>, RunError> {
         if cases.is_empty() {
             return Ok(Vec::new());
         }
-        let colors = self.shader.colors_with::<N>(&self.frame(cases), noise)?;
+        let colors = self
+            .shader
+            .colors_with::<N>(&self.frame(cases), noise, deadline)?;
         let floats: usize = self.outputs.iter().map(float_count).sum();
         let outputs = (0..cases.len()).map(|case| {
             let float = |index: usize| {
@@ -91,6 +102,19 @@ impl<'a> Evaluator<'a> {
     /// The outputs in double precision with every operation rounded at random.
     pub(super) fn perturbed(&self, cases: &[Case], seed: u64) -> Result<Vec<Outputs>, RunError> {
         self.evaluate::<RandomRounding>(cases, Seed::double(seed))
+    }
+
+    /// The outputs in 160 bits, rounded to f64; `None` if they are not found in an eighth of the time that is
+    /// left.
+    pub(super) fn exact(&self, cases: &[Case]) -> Result<Option<Vec<Outputs>>, RunError> {
+        let now = Instant::now();
+        let deadline = self.shader.deadline;
+        let deadline = deadline.map(|deadline| now + deadline.saturating_duration_since(now) / 8);
+        match self.evaluate_by::<Wide>(cases, (), deadline) {
+            Ok(outputs) => Ok(Some(outputs)),
+            Err(RunError::Cpu(Failure::Timeout { .. } | Failure::TimeUp)) => Ok(None),
+            Err(error) => Err(error),
+        }
     }
 
     /// A frame with these cases.

@@ -8,18 +8,18 @@ use super::interface::Interface;
 use super::{Case, Outputs};
 use crate::run::RunError;
 
-/// A case with its outputs in f32 and in f64.
+/// A case with its outputs in f32 and the reference: the same in f64, or in 160 bits.
 #[derive(Debug, Clone)]
 pub(super) struct Measured {
     pub(super) case: Case,
     pub(super) single: Outputs,
-    pub(super) double: Outputs,
+    pub(super) reference: Outputs,
 }
 
-/// The comparison of an output in f32 with that in f64.
+/// The comparison of an output in f32 with the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Comparison {
-    /// There is nothing to compare with: f64 has no finite result, or one beyond the range of f32.
+    /// There is nothing to compare with: the reference is not finite, or beyond the range of f32.
     Undefined,
     /// f32 has NaN or infinity.
     NotFinite,
@@ -29,17 +29,17 @@ pub(super) enum Comparison {
 
 impl Measured {
     pub(super) fn compare(&self, interface: &Interface, output: usize) -> Comparison {
-        let (single, double) = (self.single[output], self.double[output]);
-        if !double.is_finite() || double.abs() > f64::from(f32::MAX) {
+        let (single, reference) = (self.single[output], self.reference[output]);
+        if !reference.is_finite() || reference.abs() > f64::from(f32::MAX) {
             Comparison::Undefined
         } else if !single.is_finite() {
             Comparison::NotFinite
         } else if interface.outputs[output].scalar == Scalar::Float {
             // f32 has no numbers between 0 and the smallest normal one.
-            let is_flushed = (single - double).abs() <= f64::from(f32::MIN_POSITIVE);
-            Comparison::Error(if is_flushed { 0.0 } else { ulps(single, double) })
+            let is_flushed = (single - reference).abs() <= f64::from(f32::MIN_POSITIVE);
+            Comparison::Error(if is_flushed { 0.0 } else { ulps(single, reference) })
         } else {
-            Comparison::Error((single - double).abs())
+            Comparison::Error((single - reference).abs())
         }
     }
 
@@ -77,10 +77,14 @@ impl Evaluator<'_> {
     /// Evaluates cases in f32 and f64.
     pub(super) fn measure(&self, cases: Vec<Case>) -> Result<Vec<Measured>, RunError> {
         let single = self.evaluate::<f32>(&cases, ())?;
-        let double = self.evaluate::<f64>(&cases, ())?;
-        let all = cases.into_iter().zip(single.into_iter().zip(double));
+        let reference = self.evaluate::<f64>(&cases, ())?;
+        let all = cases.into_iter().zip(single.into_iter().zip(reference));
         Ok(all
-            .map(|(case, (single, double))| Measured { case, single, double })
+            .map(|(case, (single, reference))| Measured {
+                case,
+                single,
+                reference,
+            })
             .collect())
     }
 
@@ -106,13 +110,13 @@ impl Evaluator<'_> {
         }
         let outputs = self.evaluate::<f64>(&neighbors, ())?;
         let mut pairs = neighbors.chunks(2).zip(outputs.chunks(2));
-        let sensitivities = measured.iter().map(|Measured { case, double, .. }| {
+        let sensitivities = measured.iter().map(|Measured { case, reference, .. }| {
             let mut found = Sensitivity {
                 condition: vec![0.0; interface.inputs.len()],
                 ulps: 0.0,
             };
             for (&at, (neighbors, outputs)) in floats.iter().zip(pairs.by_ref()) {
-                let value = double[output];
+                let value = reference[output];
                 // Zero has no relative change, and its neighbors are denormals.
                 if case[at] == 0.0 {
                     continue;
@@ -144,7 +148,7 @@ impl Evaluator<'_> {
         for seed in PERTURBATIONS {
             let perturbed = self.perturbed(&cases, seed)?;
             for ((error, perturbed), measured) in errors.iter_mut().zip(perturbed).zip(measured) {
-                *error = error.max(ulps(perturbed[output], measured.double[output]));
+                *error = error.max(ulps(perturbed[output], measured.reference[output]));
             }
         }
         Ok(errors)

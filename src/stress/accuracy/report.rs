@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use toyproof_diagnostic::{columns, grouped, magnitude, plural};
+use toyproof_eval::Wide;
 use toyproof_glsl::tree::Scalar;
 
 use super::Case;
@@ -96,11 +97,14 @@ pub struct WorstCase {
     /// The result in f32.
     pub single: f64,
     /// The reference.
-    pub double: f64,
+    pub reference: f64,
     /// The error, in units in the last place of f32.
     pub ulps: f64,
-    /// How uncertain the reference is, in the same units.
-    pub reference_ulps: f64,
+    /// The precision of the reference: 160 bits, or 53 if these take too long.
+    pub reference_bits: u32,
+    /// The error of double precision, in the same units; if the reference has it, too, as estimated by random
+    /// rounding.
+    pub double_ulps: f64,
     /// The condition number for each input component.
     pub condition: Vec<f64>,
     /// The error that rounding the inputs to f32 causes in every formula, in the same units.
@@ -189,15 +193,23 @@ impl WorstCase {
         cause: FindCause,
     ) -> Result<Self, RunError> {
         let measured = &candidate.measured;
-        let uncertain = evaluator.reference_errors(&[measured], output)?;
+        let double_ulps = match candidate.double_error {
+            Some(error) => error,
+            None => evaluator.reference_errors(&[measured], output)?[0],
+        };
         let sensitivity = candidate.sensitivity.as_ref();
         Ok(Self {
             call: interface.call(&measured.case),
             inputs: measured.case.to_vec(),
             single: measured.single[output],
-            double: measured.double[output],
+            reference: measured.reference[output],
+            reference_bits: if candidate.double_error.is_some() {
+                Wide::BITS
+            } else {
+                f64::MANTISSA_DIGITS
+            },
             ulps: candidate.error,
-            reference_ulps: uncertain.first().copied().unwrap_or(f64::INFINITY),
+            double_ulps,
             condition: sensitivity.map_or_else(Vec::new, |sensitivity| sensitivity.condition.clone()),
             inherent_ulps: sensitivity.map_or(f64::INFINITY, |sensitivity| sensitivity.ulps),
             excess: sensitivity.map_or(0.0, |sensitivity| sensitivity.excess(candidate.error)),
@@ -260,13 +272,17 @@ impl Report {
                 let numbers: Vec<_> = numbers
                     .map(|(input, number)| format!("{} {}", input.path, short(*number)))
                     .collect();
+                let double = if worst.reference_bits == f64::MANTISSA_DIGITS {
+                    "uncertain in double precision by"
+                } else {
+                    "the error of double precision is"
+                };
                 lines.push(format!(
-                    "{} for {}: condition numbers {}; the reference is certain to {} ULP, by random \
-                     rounding in double precision",
+                    "{} for {}: condition numbers {}; {double} {} ULP of float32",
                     output.path,
                     worst.call,
                     numbers.join(", "),
-                    magnitude(worst.reference_ulps)
+                    magnitude(worst.double_ulps)
                 ));
             }
         }
@@ -378,7 +394,7 @@ impl Report {
         }
         if !output.is_float {
             lines.push(format!(
-                "{path} differs from double precision by up to {}, for",
+                "{path} differs from the exact result by up to {}, for",
                 worst.ulps
             ));
         } else if worst.excess > FORMULA_EXCESS {
@@ -451,12 +467,12 @@ impl WorstCase {
             format!("    {}", self.call),
             format!(
                 "  expected {:.9e}, got {}",
-                self.double,
+                self.reference,
                 literal(scalar, self.single)
             ),
         ];
         if !output.is_float {
-            lines[1] = format!("  expected {}, got {}", self.double, self.single);
+            lines[1] = format!("  expected {}, got {}", self.reference, self.single);
         }
         lines.extend(
             self.cause

@@ -4,6 +4,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use toyproof_verify::debug::ulps;
+
 use super::Case;
 use super::domain::Domain;
 use super::evaluator::Evaluator;
@@ -18,14 +20,15 @@ const BATCH: usize = 1 << 14;
 /// The rounds of neighbors.
 const ROUNDS: usize = 14;
 
-/// The neighbors of a round in each population.
-const NEIGHBORS: usize = 4096;
+/// The neighbors of a round for each goal, of all outputs together, and of one at most.
+const ALL_NEIGHBORS: usize = 1 << 14;
+const NEIGHBORS: usize = 1 << 12;
 
 /// The cases of a population whose neighbors are tried.
 const MEMBERS: usize = 12;
 
-/// The most outputs whose worst cases are refined.
-const MAX_REFINED_OUTPUTS: usize = 4;
+/// The most outputs whose worst cases are refined: as many as a `mat4` has.
+const MAX_REFINED_OUTPUTS: usize = 16;
 
 /// The number of special cases, for each random one.
 const SPECIAL_SHARE: f64 = 0.25;
@@ -33,9 +36,12 @@ const SPECIAL_SHARE: f64 = 0.25;
 /// The evaluations in f64 that a round spends on sensitivities.
 const SENSITIVITY_EVALUATIONS: usize = 1 << 15;
 
-/// A case counts only if the uncertainty of its reference is at most this share of its error, and of the
-/// reference itself, which has the unit of the error.
+/// A case is certain if the uncertainty of its reference in f64 is at most this share of its error, and of
+/// the reference itself, which has the unit of the error. Others are compared with exact results.
 const MAX_REFERENCE_SHARE: f64 = 0.125;
+
+/// The most time for exact results of uncertain cases: a function that takes long has only certain ones.
+const MAX_EXACT_TIME: Duration = Duration::from_secs(1);
 
 /// The least number of units in the last place that a normal f32 has.
 const ULPS_OF_REFERENCE: f64 = (1u32 << (f32::MANTISSA_DIGITS - 1)) as f64;
@@ -57,8 +63,25 @@ enum Goal {
 pub(super) struct Candidate {
     pub(super) measured: Measured,
     pub(super) error: f64,
+    /// The error of f64 in units in the last place of f32, if the reference has 160 bits.
+    pub(super) double_error: Option<f64>,
     pub(super) sensitivity: Option<Sensitivity>,
     score: f64,
+}
+
+impl Candidate {
+    fn new(measured: Measured, error: f64, sensitivity: Option<Sensitivity>) -> Self {
+        let score = sensitivity
+            .as_ref()
+            .map_or(error, |sensitivity| sensitivity.excess(error));
+        Self {
+            measured,
+            error,
+            double_error: None,
+            sensitivity,
+            score,
+        }
+    }
 }
 
 /// What is found.
@@ -120,6 +143,7 @@ pub(super) fn search(
             evaluated: 0,
             is_cut: false,
         },
+        exact_time: Duration::ZERO,
     };
     let check = || {
         if limits.interrupt.load(Ordering::Relaxed) {
@@ -132,12 +156,13 @@ pub(super) fn search(
         let is_special = !first.is_empty();
         let share = if is_special { SPECIAL_SHARE } else { 1.0 };
         let mut left = (limits.cases as f64 * share).ceil() as usize;
-        while left > 0 {
+        while left > 0 && !search.found.is_cut {
             check()?;
             let count = left.min(BATCH);
             let cases = (0..count).map(|_| kind(&mut search.sampler)).collect();
             first.extend(search.measure(cases)?);
             left -= count;
+            search.found.is_cut = limits.time.is_some_and(|limit| start.elapsed() > limit / 2);
         }
         if !is_special {
             search.found.random.clone_from(&first);
@@ -161,7 +186,9 @@ pub(super) fn search(
             break;
         }
     }
-    search.finish(&populations)?;
+    for population in populations {
+        search.keep(population)?;
+    }
     Ok(search.found)
 }
 
@@ -177,6 +204,8 @@ struct Search<'a> {
     interface: &'a Interface,
     sampler: Sampler<'a>,
     found: Found,
+    /// The time that exact results of uncertain cases took.
+    exact_time: Duration,
 }
 
 impl Search<'_> {
@@ -191,7 +220,7 @@ impl Search<'_> {
                         worst.not_finite.get_or_insert_with(|| one.clone());
                     }
                     Comparison::Error(_) => {
-                        let absolute = (one.single[output] - one.double[output]).abs();
+                        let absolute = (one.single[output] - one.reference[output]).abs();
                         worst.absolute = worst.absolute.max(absolute);
                     }
                     Comparison::Undefined => {}
@@ -203,22 +232,14 @@ impl Search<'_> {
 
     /// The populations that begin with the first cases.
     fn populations(&mut self, first: &[Measured]) -> Result<Vec<Population>, RunError> {
-        let mut ranked: Vec<(usize, Vec<&Measured>)> = (0..self.interface.outputs.len())
-            .map(|output| {
-                let error = |one: &Measured| one.error(self.interface, output);
-                let mut sorted: Vec<_> = first.iter().filter(|one| error(one).is_some()).collect();
-                sorted.sort_by(|a, b| error(b).unwrap_or(0.0).total_cmp(&error(a).unwrap_or(0.0)));
-                (output, sorted)
-            })
-            .filter(|(_, sorted)| !sorted.is_empty())
-            .collect();
-        let largest = |(output, sorted): &(usize, Vec<&Measured>)| {
-            sorted
-                .first()
-                .and_then(|one| one.error(self.interface, *output))
-                .unwrap_or(0.0)
-        };
-        ranked.sort_by(|a, b| largest(b).total_cmp(&largest(a)));
+        let ranked = (0..self.interface.outputs.len()).map(|output| {
+            let error = |one| Some((Measured::error(one, self.interface, output)?, one));
+            let mut sorted: Vec<(f64, &Measured)> = first.iter().filter_map(error).collect();
+            sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
+            (output, sorted)
+        });
+        let mut ranked: Vec<_> = ranked.filter(|(_, sorted)| !sorted.is_empty()).collect();
+        ranked.sort_by(|(_, a), (_, b)| b[0].0.total_cmp(&a[0].0));
         let mut populations = Vec::new();
         for (rank, (output, sorted)) in ranked.into_iter().enumerate() {
             for goal in [Goal::Error, Goal::Excess] {
@@ -226,7 +247,7 @@ impl Search<'_> {
                 let room = self.room(goal);
                 let (worst, spread) = (sorted.iter().take(room / 2), sorted.len().div_ceil(room));
                 let others = sorted.iter().skip(room / 2).step_by(spread.max(1)).take(room / 2);
-                let start: Vec<Measured> = worst.chain(others).map(|&one| one.clone()).collect();
+                let start: Vec<Measured> = worst.chain(others).map(|&(_, one)| one.clone()).collect();
                 let mut population = Population {
                     output,
                     goal,
@@ -236,7 +257,7 @@ impl Search<'_> {
                 if rank < MAX_REFINED_OUTPUTS {
                     populations.push(population);
                 } else {
-                    self.keep(&population);
+                    self.keep(population)?;
                 }
             }
         }
@@ -245,9 +266,11 @@ impl Search<'_> {
 
     /// The number of candidates of a round.
     fn room(&self, goal: Goal) -> usize {
+        let outputs = self.interface.outputs.len().min(MAX_REFINED_OUTPUTS);
+        let most = (ALL_NEIGHBORS / outputs).min(NEIGHBORS);
         match goal {
-            Goal::Error => NEIGHBORS,
-            Goal::Excess => (SENSITIVITY_EVALUATIONS / (2 * self.interface.inputs.len())).min(NEIGHBORS),
+            Goal::Error => most,
+            Goal::Excess => (SENSITIVITY_EVALUATIONS / (2 * self.interface.inputs.len())).min(most),
         }
     }
 
@@ -285,58 +308,82 @@ impl Search<'_> {
                 all.into_iter().map(Some).collect()
             }
         };
-        let candidates = measured
-            .into_iter()
-            .zip(sensitivities)
-            .map(|((error, measured), sensitivity)| {
-                let score = sensitivity
-                    .as_ref()
-                    .map_or(error, |sensitivity| sensitivity.excess(error));
-                Candidate {
-                    measured,
-                    error,
-                    sensitivity,
-                    score,
-                }
-            });
+        let candidates = measured.into_iter().zip(sensitivities);
+        let candidates =
+            candidates.map(|((error, measured), sensitivity)| Candidate::new(measured, error, sensitivity));
         let mut best: Vec<Candidate> = candidates.collect();
         best.sort_by(|a, b| b.score.total_cmp(&a.score));
         best.truncate(4 * MEMBERS);
         let cases: Vec<&Measured> = best.iter().map(|one| &one.measured).collect();
-        let uncertain = self.evaluator.reference_errors(&cases, output)?;
-        let known = best.into_iter().zip(uncertain);
-        let known = known
-            .filter(|(one, uncertain)| *uncertain <= MAX_REFERENCE_SHARE * one.error.min(ULPS_OF_REFERENCE));
+        let uncertainties = self.evaluator.reference_errors(&cases, output)?;
+        let mut uncertain = Vec::new();
+        for (one, uncertainty) in best.into_iter().zip(uncertainties) {
+            let is_certain = uncertainty <= MAX_REFERENCE_SHARE * one.error.min(ULPS_OF_REFERENCE);
+            let kept = if is_certain {
+                &mut population.members
+            } else {
+                &mut uncertain
+            };
+            kept.push(one);
+        }
+        uncertain.truncate(MEMBERS);
+        if self.exact_time < MAX_EXACT_TIME {
+            let start = Instant::now();
+            let confirmed = self.compared_exactly(uncertain, output)?;
+            population.members.extend(confirmed.unwrap_or_default());
+            self.exact_time += start.elapsed();
+        }
         let members = &mut population.members;
-        members.extend(known.map(|(one, _)| one));
         members.sort_by(|a, b| b.score.total_cmp(&a.score));
         members.dedup_by(|a, b| a.measured.case == b.measured.case);
         members.truncate(MEMBERS);
         Ok(())
     }
 
-    /// Keeps the best member of a population.
-    fn keep(&mut self, population: &Population) {
-        let worst = &mut self.found.outputs[population.output];
-        let best = population.members.first().cloned();
+    /// Keeps the best member of a population: of those with exact results, where these are found in time.
+    fn keep(&mut self, mut population: Population) -> Result<(), RunError> {
+        let output = population.output;
+        if let Some(compared) = self.compared_exactly(population.members.clone(), output)? {
+            population.members = compared;
+            population.members.sort_by(|a, b| b.score.total_cmp(&a.score));
+        }
+        let mut best = population.members.into_iter().next();
+        if let Some(candidate) = best.as_mut().filter(|best| best.sensitivity.is_none()) {
+            let one = [&candidate.measured];
+            let found = self.evaluator.sensitivities(self.interface, &one, output)?;
+            candidate.sensitivity = found.into_iter().next();
+        }
+        let worst = &mut self.found.outputs[output];
         match population.goal {
             Goal::Error => worst.error = best,
             Goal::Excess => worst.excess = best,
         }
+        Ok(())
     }
 
-    /// Keeps the best members of all populations, with their sensitivities.
-    fn finish(&mut self, populations: &[Population]) -> Result<(), RunError> {
-        for population in populations {
-            self.keep(population);
-        }
-        for output in 0..self.found.outputs.len() {
-            if let Some(candidate) = &mut self.found.outputs[output].error {
-                let one = [&candidate.measured];
-                let found = self.evaluator.sensitivities(self.interface, &one, output)?;
-                candidate.sensitivity = found.into_iter().next();
-            }
-        }
-        Ok(())
+    /// The candidates compared with results in 160 bits, without those that have none; `None` if these are
+    /// not found in time.
+    fn compared_exactly(
+        &self,
+        candidates: Vec<Candidate>,
+        output: usize,
+    ) -> Result<Option<Vec<Candidate>>, RunError> {
+        let cases: Vec<Case> = candidates.iter().map(|one| one.measured.case.clone()).collect();
+        let Some(exact) = self.evaluator.exact(&cases)? else {
+            return Ok(None);
+        };
+        let compared = candidates.into_iter().zip(exact);
+        let compared = compared.filter_map(|(mut one, exact)| {
+            let double_error = one
+                .double_error
+                .unwrap_or_else(|| ulps(one.measured.reference[output], exact[output]));
+            one.measured.reference = exact;
+            let error = one.measured.error(self.interface, output)?;
+            Some(Candidate {
+                double_error: Some(double_error),
+                ..Candidate::new(one.measured, error, one.sensitivity)
+            })
+        });
+        Ok(Some(compared.collect()))
     }
 }

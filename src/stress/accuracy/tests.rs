@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use toyproof_diagnostic::{File, Files};
+use toyproof_eval::Wide;
 use toyproof_glsl::{self as glsl, Checked};
 
 use super::*;
@@ -189,4 +190,26 @@ fn what_cannot_be_examined_is_refused() {
     assert_eq!(refused("none"), "none has no inputs to vary");
     assert!(refused("look").contains("the parameter `s` of type sampler2D"));
     assert_eq!(refused("lok"), "there is no function `lok`; did you mean `look`?");
+}
+
+#[test]
+fn the_reported_reference_has_more_digits_than_f64() {
+    // For x below 1e-8, the cosine is 1 in f64, too. (1 − cos x) / x² is nearly 1/2.
+    let text = "float half_versed(float x) { return (1.0 - cos(x)) / (x * x); }";
+    let report = examined(text, "half_versed", &[("x", "1e-9..1e-7")], &[]);
+    let evaluator = |text: &str| {
+        let checked = checked(text);
+        let interface = Interface::new(&checked, "half_versed").unwrap();
+        let evaluator = Evaluator::new(text, &checked, &interface, None).unwrap();
+        let case: Case = vec![f64::from(1e-9f32)].into();
+        let double = evaluator
+            .evaluate::<f64>(std::slice::from_ref(&case), ())
+            .unwrap();
+        let exact = evaluator.exact(&[case]).unwrap().unwrap();
+        [double[0][0], exact[0][0]]
+    };
+    assert_eq!(evaluator(&shader(text)), [0.0, 0.5]);
+    let worst = report.outputs[0].worst.as_ref().unwrap();
+    assert_eq!((worst.reference_bits, worst.single), (Wide::BITS, 0.0));
+    assert!((worst.reference - 0.5).abs() < 1e-12, "{worst:?}");
 }

@@ -115,8 +115,8 @@ apply! {
     IsInf(a: F) W = |_| bool_word(a.abs() == N::from_f64(f64::INFINITY));
     FromInt(a: W) F = |_| N::from_f64(f64::from(a.cast_signed()));
     FromUint(a: W) F = |_| N::from_f64(f64::from(a));
-    ToInt(a: F) W = |_| to_int(a.to_f64()).cast_unsigned();
-    ToUint(a: F) W = |_| to_uint(a.to_f64());
+    ToInt(a: F) W = |_| to_int(a.trunc().to_f64()).cast_unsigned();
+    ToUint(a: F) W = |_| to_uint(a.trunc().to_f64());
     FromBits(a: W) F = |_| N::from_f32(f32::from_bits(a));
     ToBits(a: F) W = |_| a.to_f32().to_bits();
     PackHalf(a: F, b: F) W = |_| u32::from(f32_to_f16(a.to_f32())) | u32::from(f32_to_f16(b.to_f32())) << 16;
