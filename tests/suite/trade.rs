@@ -261,6 +261,29 @@ fn named_parameters_are_varied() {
 }
 
 #[test]
+fn parameters_in_included_files_change_the_image() {
+    let (included, image) = MARCH.split_once("const float HIT").unwrap();
+    let image = format!("#include \"march.h\"\nconst float HIT{image}");
+    let project = [
+        ("p/march.h", included),
+        ("p/common.glsl", "const float SCALE = 1.0;\n"),
+        ("p/image.glsl", &image),
+    ];
+    let shader = [("march.h", included), ("a.glsl", &image)];
+    for (files, subject) in [(&project[..], "p"), (&shader, "a.glsl")] {
+        let (_, json) = settings_of(files, &[subject, "--vary", "MAX_STEPS=1,2", "--size", "32x18"]);
+        let values = values_of(&json, "MAX_STEPS");
+        assert!(!values.is_empty(), "{subject}: {json:#}");
+        for (value, one) in values {
+            assert!(
+                one["error"]["differing_pixels_8bit"].as_u64() > Some(0),
+                "{subject}, {value}: {one:#}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_shader_or_a_scene_is_the_reference() {
     let few = MARCH.replace("256", "4");
     let files = [("few.glsl", few.as_str()), ("many.glsl", MARCH)];

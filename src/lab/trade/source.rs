@@ -1,6 +1,9 @@
 //! The shader or project to measure: its text with other settings, compiled for all renderers.
 
+use std::collections::BTreeMap;
+use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use toyproof_diagnostic::{File, FileId, Files, Span};
@@ -118,11 +121,17 @@ impl<'a> Source<'a> {
                 let mut files = files.clone();
                 let mut changed: Vec<FileId> = literals.iter().map(|(span, _)| span.file).collect();
                 changed.dedup();
+                let mut included = BTreeMap::new();
                 for file in changed {
                     let text = edited(&files, file, &literals);
+                    // Included files are read again, by their paths.
+                    if let Ok(path) = Path::new(files.get(file).name()).canonicalize() {
+                        included.insert(path, text.clone());
+                    }
                     files.replace(file, text);
                 }
-                let edited = project.recompile(includes, &mut files, &options).ok()?;
+                let includes = includes.map(|includes| includes.clone().with_open_texts(Arc::new(included)));
+                let edited = project.recompile(includes.as_ref(), &mut files, &options).ok()?;
                 let passes = edited.checked_of(rendering).cloned().collect();
                 let frames = Frames {
                     rendering: Rc::new(rendering.clone()),
