@@ -108,8 +108,7 @@ impl Wide {
         )
     }
 
-    /// A result; `otherwise` is that for operands which have no arithmetic, such as infinities, or whose
-    /// result is none.
+    /// A result; `otherwise` where the library has none, as beyond a function's domain.
     fn result(result: FpResult<Big>, otherwise: f64) -> Self {
         match result {
             Ok(big) => Self::new(big.value()),
@@ -290,9 +289,10 @@ impl Arithmetic for Wide {
             let (y, x) = (y[lane], x[lane]);
             let of_classes = libm::atan2(y.class, x.class);
             if y.is_regular() && x.is_regular() {
-                let constants = |cache: &mut ConstCache| CONTEXT.atan2(&y.repr(), &x.repr(), Some(cache));
-                return Self::result(CONSTANTS.with_borrow_mut(constants), of_classes);
+                let angle = |cache: &mut ConstCache| CONTEXT.atan2(&y.repr(), &x.repr(), Some(cache));
+                return Self::result(CONSTANTS.with_borrow_mut(angle), of_classes);
             }
+            // An axis or a diagonal: a number of eighths of a turn.
             let eighths = (of_classes / FRAC_PI_4).round();
             if of_classes == 0.0 || eighths.is_nan() {
                 return Self::special(of_classes);
@@ -372,6 +372,7 @@ mod tests {
         for exponent in 100..300 {
             let small = wide(0.1 * 2f64.powi(-exponent));
             for sum in [wide(1.0).add(small, ()), wide(1.0).sub(small, ())] {
+                // Half a unit in the last place of a number from 1 to 2.
                 let error = sum.sub(wide(1.0), ()).abs().sub(small, ()).abs();
                 assert!(error <= wide(2f64.powi(-160)), "{exponent}: {error:?}");
             }
@@ -431,6 +432,7 @@ mod tests {
 
     #[test]
     fn functions_are_inverse_to_each_other_and_reduce_large_angles() {
+        // Two roundings by 2⁻¹⁶⁰, which no inverse function amplifies by more than ten here.
         let tolerance = wide(2f64.powi(-153));
         let x = wide(0.7).add(wide(1e-40), ());
         let close = |[y]: [Wide; 1]| assert!(y.sub(x, ()).abs() < tolerance, "{y:?}");

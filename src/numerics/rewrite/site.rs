@@ -13,6 +13,13 @@ const MAX_DEFINITIONS: usize = 4;
 /// The most products in each other of which the factors are one product.
 const MAX_DEPTH: usize = 8;
 
+/// The most operators and operands of an expression that is rewritten, or whose value a variable is followed
+/// to: rules compare its terms in pairs, and repeat their texts.
+const MAX_PARTS: usize = 120;
+
+/// The most places to which a number is followed.
+const MAX_PLACES: usize = 1000;
+
 /// A shader with the definitions of its variables.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
@@ -27,6 +34,8 @@ pub(super) struct Definitions<'a> {
     /// Where each variable is read or written.
     uses: HashMap<VariableId, Vec<ExprId>>,
     parents: HashMap<ExprId, ExprId>,
+    /// The expressions of at most [`MAX_PARTS`].
+    short: HashSet<ExprId>,
 }
 
 /// A term of a sum.
@@ -68,6 +77,17 @@ impl<'a> Definitions<'a> {
                 }
             });
         }
+        let mut sizes: HashMap<ExprId, usize> = HashMap::new();
+        let roots = tree.exprs.ids().filter(|id| !parents.contains_key(id));
+        for expr in roots.flat_map(|root| tree.postorder(root)) {
+            let mut size = 1;
+            tree[expr]
+                .kind
+                .for_each_operand(|operand| size += sizes.get(&operand).copied().unwrap_or(0));
+            sizes.insert(expr, size);
+        }
+        let short = sizes.into_iter().filter(|(_, size)| *size <= MAX_PARTS);
+        let short: HashSet<ExprId> = short.map(|(expr, _)| expr).collect();
         let values = tree.variables.iter().filter_map(|(id, variable)| {
             let is_local = matches!(
                 variable.kind,
@@ -78,12 +98,14 @@ impl<'a> Definitions<'a> {
                 (Some(1), None) => assigned.get(&id).copied(),
                 _ => None,
             };
-            Some((id, value.filter(|_| is_local)?))
+            Some((id, value.filter(|value| is_local && short.contains(value))?))
         });
+        let values = values.collect();
         Self {
             tree,
             text,
-            values: values.collect(),
+            values,
+            short,
             initialized: tree
                 .variables
                 .iter()
@@ -98,7 +120,7 @@ impl<'a> Definitions<'a> {
         }
     }
 
-    /// The expressions of all functions and global variables.
+    /// The expressions of all functions and global variables, without long ones.
     pub(super) fn sites(&self) -> Vec<ExprId> {
         let initializers = self
             .tree
@@ -115,6 +137,7 @@ impl<'a> Definitions<'a> {
                 }
             });
         }
+        sites.retain(|site| self.short.contains(site));
         sites.sort_unstable();
         sites.dedup();
         sites
@@ -335,6 +358,9 @@ impl<'a> Definitions<'a> {
         let mut pending = vec![literal];
         let mut seen = HashSet::new();
         while let Some(carrier) = pending.pop() {
+            if seen.len() == MAX_PLACES {
+                return false;
+            }
             if !seen.insert(carrier) {
                 continue;
             }
@@ -376,22 +402,24 @@ impl<'a> Definitions<'a> {
 
     /// Whether an expression consists of numbers, and variables with such values.
     fn is_constant(&self, expr: ExprId) -> bool {
-        self.tree
-            .postorder(expr)
-            .into_iter()
-            .all(|part| match self.tree[part].kind {
-                ExprKind::Variable(variable) => self.values.get(&variable).is_some_and(|&value| {
-                    let parts = self.tree.postorder(value);
-                    parts.into_iter().all(|part| {
-                        !matches!(
-                            self.tree[part].kind,
-                            ExprKind::Variable(_) | ExprKind::Call { .. }
-                        )
-                    })
-                }),
-                ExprKind::Call { .. } => false,
-                _ => true,
-            })
+        self.short.contains(&expr)
+            && self
+                .tree
+                .postorder(expr)
+                .into_iter()
+                .all(|part| match self.tree[part].kind {
+                    ExprKind::Variable(variable) => self.values.get(&variable).is_some_and(|&value| {
+                        let parts = self.tree.postorder(value);
+                        parts.into_iter().all(|part| {
+                            !matches!(
+                                self.tree[part].kind,
+                                ExprKind::Variable(_) | ExprKind::Call { .. }
+                            )
+                        })
+                    }),
+                    ExprKind::Call { .. } => false,
+                    _ => true,
+                })
     }
 
     /// The x of `x * x` and of `pow(x, 2.0)`.

@@ -257,6 +257,35 @@ fn only_steps_are_made_larger() {
 }
 
 #[test]
+fn long_expressions_are_left_as_they_are() {
+    let squares = vec!["x * x"; 3000].join(" + ");
+    let text = format!(
+        "void mainImage(out vec4 c, in vec2 p) {{ float x = p.x, s = sqrt({squares}), t = s - x; c = vec4(s - t); }}"
+    );
+    let mut files = Files::default();
+    let file = files.add(File::new("a.glsl", text.as_str()));
+    let subject = Subject {
+        checked: &glsl::check(&files, file, &glsl::Options::default()).unwrap(),
+        text: &text,
+        frame: &Frame::default(),
+        near: None,
+        max_candidates: usize::MAX,
+    };
+    let found = candidates(&subject);
+    let bytes: usize = found
+        .iter()
+        .flat_map(|one| &one.edits)
+        .map(|edit| edit.replacement.len())
+        .sum();
+    // Those of the root alone would have hundreds of megabytes.
+    assert!(
+        !found.is_empty() && bytes < 1 << 20,
+        "{} forms, {bytes} bytes",
+        found.len()
+    );
+}
+
+#[test]
 fn rounding_that_no_identity_avoids_is_left() {
     let found = rewritten("", "fract(sin(x * 1000.0) * 4375800.5453)");
     assert!(found.fix.is_none() && found.before.imprecise > 0, "{found:?}");
