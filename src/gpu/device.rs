@@ -168,8 +168,9 @@ impl Device {
     fn from_adapter(adapter: Adapter) -> Result<Self, Failure> {
         let filterable = adapter.features() & Features::FLOAT32_FILTERABLE;
         let blendable = adapter.features() & Features::FLOAT32_BLENDABLE;
+        let halves = adapter.features() & Features::SHADER_F16;
         let descriptor = wgpu::DeviceDescriptor {
-            required_features: Features::PASSTHROUGH_SHADERS | filterable | blendable,
+            required_features: Features::PASSTHROUGH_SHADERS | filterable | blendable | halves,
             required_limits: adapter.limits(),
             ..Default::default()
         };
@@ -202,6 +203,11 @@ impl Device {
     /// Returns the name of the adapter, without versions.
     pub(super) fn adapter_name(&self) -> String {
         self.adapter.get_info().name
+    }
+
+    /// Returns whether shaders may compute in floats of 16 bits.
+    pub(super) fn has_halves(&self) -> bool {
+        self.gpu.features().contains(Features::SHADER_F16)
     }
 
     /// Returns whether a workaround is applied on this device.

@@ -33,13 +33,23 @@ pub(super) struct Program {
     channels: [Shape; 4],
     sampling: [Sampling; 4],
     float: FloatMode,
+    /// Whether the device must have floats of 16 bits.
+    has_halves: bool,
 }
 
 impl Program {
     /// Translates a lowered shader, and returns its module, too.
     pub(super) fn of(lowered: &Lowered, float: FloatMode) -> Result<(Self, ValidModule), Failure> {
         let module = ValidModule::parse(lowered).map_err(refused)?;
-        let program = Self::new(&module, float)?.with_sampling(lowered.sampling());
+        let mut words = spirv::words(&module).map_err(naga_failed)?;
+        if lowered.is_narrowed() {
+            words = spirv::narrowed(&words);
+        }
+        let program = Self {
+            sampling: lowered.sampling(),
+            has_halves: lowered.is_narrowed(),
+            ..Self::from_words(words, module.channels(), float)
+        };
         Ok((program, module))
     }
 
@@ -64,6 +74,7 @@ impl Program {
             channels,
             sampling: [Sampling::default(); 4],
             float,
+            has_halves: false,
         }
     }
 
@@ -99,6 +110,12 @@ impl Device {
 
     /// Creates the pipeline; the driver may compile it at the first draw.
     pub(super) fn compile(&self, program: &Program) -> Result<CompiledPipeline, Failure> {
+        if program.has_halves && !self.has_halves() {
+            return Err(Failure::NoDriver(format!(
+                "{} has no floats of 16 bits",
+                self.adapter_name()
+            )));
+        }
         self.with_error_scopes(|| {
             let layout = Layout::new(self, program.channels);
             let words = with_workarounds(&program.words, &self.adapter_name(), program.float);

@@ -60,7 +60,8 @@
 //! - [`wgsl`]: the tree as WGSL that its author recognizes, for several kinds of host.
 //! - [`c_family`]: the tree as HLSL that its author recognizes, for several hosts.
 //! - [`naga_ir`]: naga's parsers and its validator.
-//! - [`backend`]: SPIR-V, either strict or as naga writes it; WGSL, MSL, HLSL and GLSL.
+//! - [`backend`]: SPIR-V, either strict or as naga writes it, also with floats of 16 bits; WGSL, MSL, HLSL and
+//!   GLSL.
 //! - `inexact`: the list of functions whose last bits are implementation-defined.
 
 #![cfg_attr(

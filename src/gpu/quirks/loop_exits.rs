@@ -2,9 +2,9 @@
 //! [`LOOP_EXITS`](super::LOOP_EXITS).
 
 use spirv::Op;
-use toyproof_translate::backend::spirv::{instructions, opcode};
+use toyproof_translate::backend::spirv::{instructions, opcode, push};
 
-use super::opaque::{Opaque, functions_start, push};
+use super::opaque::{Opaque, functions_start};
 
 /// Adds an exit that is never taken to the head of each loop that may assign a variable before its first
 /// exit.

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use spirv::{BuiltIn, Decoration, Op};
-use toyproof_translate::backend::spirv::{BOUND, instructions, opcode};
+use toyproof_translate::backend::spirv::{BOUND, instructions, opcode, push};
 
 /// The ids of a module that are needed to compute such zeros, and the types that are added for it.
 pub(super) struct Opaque {
@@ -129,12 +129,6 @@ pub(super) fn functions_start(words: &[u32]) -> usize {
     let mut all = instructions(words);
     let first = all.find(|(_, instruction)| opcode(instruction) == Some(Op::Function));
     first.map_or(words.len(), |(at, _)| at)
-}
-
-/// Appends an instruction.
-pub(super) fn push(code: &mut Vec<u32>, op: Op, operands: &[u32]) {
-    code.push((operands.len() as u32 + 1) << 16 | op as u32);
-    code.extend(operands);
 }
 
 /// The words of a valid shader.

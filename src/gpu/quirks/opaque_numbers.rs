@@ -3,10 +3,10 @@
 use std::collections::{HashMap, HashSet};
 
 use spirv::{GlslStd450Op, Op, StorageClass};
-use toyproof_translate::backend::spirv::{has_type, instructions, is_product, opcode};
+use toyproof_translate::backend::spirv::{has_type, instructions, is_product, opcode, push};
 
 use super::foldable::{Foldable, Known, Operands};
-use super::opaque::{Opaque, functions_start, push};
+use super::opaque::{Opaque, functions_start};
 
 /// Combines some numbers by or with the bits of `gl_FragCoord.z`, which are 0 if an image is
 /// rendered with triangles at depth 0. Their values do not change; neither does a module without

@@ -242,9 +242,25 @@ pub struct Lowered {
     too_deep: Option<Diagnostic>,
     checks_fetches: bool,
     sampling: [Sampling; 4],
+    is_narrowed: bool,
 }
 
 impl Lowered {
+    /// The shader for drivers that compute in 16 bits what it rounds to 16 bits: see
+    /// [`narrowed`](crate::backend::spirv::narrowed).
+    #[must_use]
+    pub fn narrowed(self) -> Self {
+        Self {
+            is_narrowed: true,
+            ..self
+        }
+    }
+
+    /// Whether drivers compute in 16 bits what it rounds to 16 bits.
+    pub fn is_narrowed(&self) -> bool {
+        self.is_narrowed
+    }
+
     /// The text that naga parses.
     pub fn text(&self) -> &str {
         &self.text

@@ -18,7 +18,7 @@ pub(super) fn import(spirv: &[u32]) -> Option<u32> {
 }
 
 /// Decodes a string literal: bytes in words, up to a zero.
-fn text(words: &[u32]) -> String {
+pub(super) fn text(words: &[u32]) -> String {
     let bytes = words.iter().flat_map(|word| word.to_le_bytes());
     let text: Vec<u8> = bytes.take_while(|&byte| byte != 0).collect();
     String::from_utf8_lossy(&text).into_owned()

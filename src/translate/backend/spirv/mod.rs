@@ -2,6 +2,7 @@
 
 mod expand;
 mod link;
+mod narrow;
 
 use std::collections::HashSet;
 
@@ -9,6 +10,7 @@ use ::spirv::{Capability, Decoration, GlslStd450Op, Op};
 pub use expand::expanded;
 use naga::ShaderStage;
 use naga::back::spv::{BindingInfo, Options, PipelineOptions, WriterFlags, write_vec};
+pub use narrow::{ROUNDING_FUNCTION, narrowed};
 
 use super::{ENTRY_POINT, bindings, bounds};
 use crate::TranslateError;
@@ -110,6 +112,12 @@ pub fn of_bytes(bytes: &[u8]) -> Option<Vec<u32>> {
             .map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]]))
             .collect()
     })
+}
+
+/// Appends an instruction.
+pub fn push(code: &mut Vec<u32>, op: Op, operands: &[u32]) {
+    code.push((1 + operands.len() as u32) << 16 | op as u32);
+    code.extend(operands);
 }
 
 /// The opcode of an instruction, if known.
