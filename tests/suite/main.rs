@@ -53,6 +53,7 @@ mod generated;
 mod glslang;
 mod grading;
 mod growth;
+mod halves;
 mod hosted;
 mod hostile;
 mod hostile_class;

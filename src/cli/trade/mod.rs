@@ -64,7 +64,7 @@ pub(in crate::cli) struct Args {
     /// Instead of measuring, look for variables that may be `mediump`: numbers of 16 bits
     ///
     /// Emulates 16 bits to the bit, and writes the shader with the qualifiers that change at most 0.1 % of the
-    /// pixels visibly: mediump.glsl.
+    /// pixels visibly: mediump.glsl. GPUs that have such numbers render it in 16 bits, too.
     #[arg(long, conflicts_with_all = ["vary", "reference", "max_error"])]
     mediump: bool,
     /// Compare with this scene, or with this shader in double precision

@@ -3,6 +3,7 @@
 
 mod advice;
 mod features;
+mod half;
 mod method;
 mod parameter;
 mod reference;
@@ -15,11 +16,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 pub use features::{FeatureReport, FeatureSubject, features};
+pub use half::{Evaluated, HalfRun, half_run};
 pub use method::Configuration;
 use method::{Backend, Group, Method, RenderContext};
 pub use parameter::{Setting, Vary, VaryError, VaryParseError};
 pub use reference::ErrorStatistics;
-use reference::{Reference, visible_pixels};
+use reference::Reference;
 use schedule::{Cost, RunKind, Runner};
 pub use schedule::{TimeStatistics, median};
 pub use screening::Tried;
@@ -33,6 +35,7 @@ use toyproof_gpu::Worker;
 use toyproof_image::{Frame, Image};
 use toyproof_scene::Scene;
 use toyproof_stress as stress;
+use toyproof_verify::compare::visible_pixels;
 
 /// The scene or shader to measure.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use toyproof_image::{Frame, Image};
 use toyproof_metrics::{Metric, measure};
 use toyproof_scene::{Requirements, Sampler, Scene};
 use toyproof_tracer::Tracer;
-use toyproof_verify::compare::{self, PixelStatus, TOLERANCE};
+use toyproof_verify::compare::{self, TOLERANCE, visible_pixels};
 
 use super::method::RenderContext;
 use super::source::Shader;
@@ -151,16 +151,6 @@ const ROUNDING_COST: f64 = 3.0;
 
 /// The share of visible pixels between f32 and f64 from which f64 is not what a shader is to show.
 const MAX_ROUNDED_SHARE: f64 = 0.01;
-
-/// The number of pixels of two images whose difference is visible.
-pub(super) fn visible_pixels(one: &Image, other: &Image) -> u64 {
-    let undefined = vec![false; one.pixels().len()];
-    let statuses = compare::precision(one, other, &undefined);
-    statuses
-        .iter()
-        .filter(|status| **status == PixelStatus::Differs)
-        .count() as u64
-}
 
 // Errors of images relative to the reference.
 

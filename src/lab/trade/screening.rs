@@ -7,10 +7,10 @@ use std::time::{Duration, Instant};
 use serde::Serialize;
 use toyproof_glsl as glsl;
 use toyproof_image::{Frame, Image};
+use toyproof_verify::compare::visible_pixels;
 
 use super::advice::INVISIBLE_SHARE;
 use super::parameter::{Parameter, Setting, Vary, VaryError, proposals, shown};
-use super::reference::visible_pixels;
 use super::source::{Shader, Source};
 
 /// The largest number of pixels of the small images.

@@ -3,18 +3,20 @@
 //! et al., SC 2013), on images in which 16 bits are emulated to the bit.
 
 mod emulation;
+mod library;
 mod unit;
 
+use std::collections::HashSet;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use serde::Serialize;
-use toyproof_diagnostic::{Deadline, File, Files};
 use toyproof_eval::{Settings, UndefinedPolicy};
 use toyproof_eval_native::Program;
-use toyproof_glsl::{self as glsl, Checked};
+use toyproof_glsl::Checked;
+use toyproof_glsl::tree::ExprId;
 use toyproof_image::{Frame, Image};
-use toyproof_verify::compare::{PixelStatus, precision};
+use toyproof_verify::compare::visible_pixels;
 
 use self::emulation::Emulation;
 use self::unit::{Unit, units};
@@ -23,10 +25,12 @@ use self::unit::{Unit, units};
 const MAX_SHARE: f64 = 0.001;
 
 /// What may be `mediump`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 pub struct MixedPrecision {
     /// The names of the variables, and of the functions whose results may be.
     pub names: Vec<String>,
+    /// Their number; several variables may have one name.
+    pub found: usize,
     /// The number of variables and results that were tried.
     pub tried: usize,
     /// The share of the operations that the pixels execute which have 16 bits then; `None` if they cannot be
@@ -39,14 +43,24 @@ pub struct MixedPrecision {
     /// The shader with the qualifiers.
     #[serde(skip)]
     pub text: String,
+    /// The image of the shader as it is.
+    #[serde(skip)]
+    pub own: Image,
+    /// The shader that rounds to 16 bits what may have 16 bits.
+    #[serde(skip)]
+    pub emulated: Checked,
+    /// Its image.
+    #[serde(skip)]
+    pub image: Image,
 }
 
 /// Images of a shader in which some declarations have 16 bits.
 struct Trials<'a> {
     checked: &'a Checked,
-    text: &'a str,
     frame: &'a Frame,
     own: Image,
+    /// The image with what is accepted.
+    image: Image,
     deadline: Instant,
     interrupt: &'a AtomicBool,
     is_over: bool,
@@ -66,8 +80,8 @@ pub fn mixed_precision(
     let units = units(checked, text);
     let mut trials = Trials {
         checked,
-        text,
         frame,
+        image: own.clone(),
         own,
         deadline,
         interrupt,
@@ -75,17 +89,22 @@ pub fn mixed_precision(
     };
     let mut accepted = Vec::new();
     trials.bisect(&units, &mut accepted);
-    let changed_pixels = trials.changed(&accepted).unwrap_or(0);
+    let emulation = Emulation::new(checked, accepted.iter().copied());
+    let count = |units: &mut dyn Iterator<Item = &Unit>| units.map(|unit| unit.names.len()).sum();
     let mut names: Vec<String> = accepted.iter().flat_map(|unit| unit.names.clone()).collect();
     names.sort();
     names.dedup();
     Some(MixedPrecision {
         names,
-        tried: units.iter().map(|unit| unit.names.len()).sum(),
-        operations: trials.executed(&accepted),
-        changed_pixels,
+        found: count(&mut accepted.iter().copied()),
+        tried: count(&mut units.iter()),
+        operations: trials.executed(&emulation.operations),
+        changed_pixels: visible_pixels(&trials.own, &trials.image),
         is_complete: !trials.is_over,
         text: qualified(text, &accepted),
+        own: trials.own,
+        emulated: emulation.shader(),
+        image: trials.image,
     })
 }
 
@@ -101,31 +120,8 @@ fn render(checked: &Checked, frame: &Frame, deadline: Instant) -> Option<Image> 
 }
 
 impl<'a> Trials<'a> {
-    /// The number of pixels that visibly change; `None` if the time is over, or if the emulation does not
-    /// compile.
-    fn changed(&self, units: &[&Unit]) -> Option<u64> {
-        let text = Emulation::new(self.checked, self.text, units.iter().copied()).text();
-        let mut files = Files::default();
-        let file = files.add(File::new("<mediump>", text));
-        let options = glsl::Options {
-            deadline: Deadline::after(self.deadline.saturating_duration_since(Instant::now())),
-            ..self.checked.options()
-        };
-        let checked = glsl::check(&files, file, &options).ok()?;
-        let image = render(&checked, self.frame, self.deadline)?;
-        let undefined = vec![false; image.pixels().len()];
-        let statuses = precision(&self.own, &image, &undefined);
-        Some(
-            statuses
-                .iter()
-                .filter(|status| **status == PixelStatus::Differs)
-                .count() as u64,
-        )
-    }
-
     /// The share of the executed operations that have 16 bits; `None` if they cannot be counted in time.
-    fn executed(&self, units: &[&Unit]) -> Option<f64> {
-        let medium = Emulation::new(self.checked, self.text, units.iter().copied()).operations;
+    fn executed(&self, medium: &HashSet<ExprId>) -> Option<f64> {
         let limit = self.deadline.saturating_duration_since(Instant::now());
         let program = Program::within(self.checked, limit).ok()?;
         let settings = Settings {
@@ -149,9 +145,13 @@ impl<'a> Trials<'a> {
             self.is_over = true;
             return;
         }
-        let all: Vec<&Unit> = accepted.iter().copied().chain(units).collect();
+        let all = accepted.iter().copied().chain(units);
+        let emulated = Emulation::new(self.checked, all).shader();
         let limit = MAX_SHARE * self.own.pixels().len() as f64;
-        if self.changed(&all).is_some_and(|changed| changed as f64 <= limit) {
+        let image = render(&emulated, self.frame, self.deadline);
+        let image = image.filter(|image| visible_pixels(&self.own, image) as f64 <= limit);
+        if let Some(image) = image {
+            self.image = image;
             accepted.extend(units);
         } else if units.len() > 1 {
             let (first, second) = units.split_at(units.len() / 2);
@@ -174,6 +174,9 @@ fn qualified(text: &str, units: &[&Unit]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use toyproof_diagnostic::{File, Files};
+    use toyproof_glsl as glsl;
+
     use super::*;
 
     fn check(text: &str) -> (Checked, Files) {
@@ -185,27 +188,28 @@ mod tests {
         )
     }
 
-    /// The color of the first pixel with all declarations in 16 bits.
-    fn emulated(body: &str) -> [f32; 3] {
+    /// The color of the first pixel of a body of `mainImage`, as it is and with all declarations in 16 bits.
+    fn colors(body: &str) -> [[f32; 3]; 2] {
         let text = format!(
             "float square(float x) {{ return x * x; }} void mainImage(out vec4 c, in vec2 p) {{ {body} }}"
         );
         let (checked, _) = check(&text);
         let units = units(&checked, &text);
-        let text = Emulation::new(&checked, &text, &units).text();
-        let (checked, _) = check(&text);
+        let emulated = Emulation::new(&checked, &units).shader();
         let frame = Frame {
             size: [1, 1],
             ..Frame::default()
         };
-        let image = render(
-            &checked,
-            &frame,
-            Instant::now() + std::time::Duration::from_secs(60),
-        )
-        .unwrap();
-        let [r, g, b, _] = image.pixels()[0];
-        [r, g, b]
+        [checked, emulated].map(|shader| {
+            let deadline = Instant::now() + std::time::Duration::from_secs(60);
+            let image = render(&shader, &frame, deadline).unwrap();
+            let [r, g, b, _] = image.pixels()[0];
+            [r, g, b]
+        })
+    }
+
+    fn emulated(body: &str) -> [f32; 3] {
+        colors(body)[1]
     }
 
     #[test]
@@ -216,12 +220,49 @@ mod tests {
             emulated("float x = 0.1; c = vec4(x, square(x), x * x, 1.0);"),
             [0.099_975_586, 0.009_994_507, 0.009_994_507]
         );
+        let limits = "float x = 2048.0; x += 1.0; vec2 v = vec2(65504.0, 1.0e-8);";
         assert_eq!(
-            emulated(
-                "float x = 2048.0; x += 1.0; vec2 v = vec2(65504.0, 1.0e-8); c = vec4(x, v.x * 2.0, v.y, 1.0);"
-            ),
+            emulated(&format!("{limits} c = vec4(x, v.x * 2.0, v.y, 1.0);")),
             [2048.0, f32::INFINITY, 0.0]
         );
+        // 300² + 300² exceeds 65504, and x − 3·⌊x/3⌋ has the rounded quotient, 3.
+        let steps = "vec2 v = vec2(300.0); float x = 8.9985, y = 3.0; x -= 0.0; v.x += 0.0;";
+        assert_eq!(
+            emulated(&format!(
+                "{steps} c = vec4(length(v), mod(x, y), dot(v, v.yx) - v.x, 1.0);"
+            )),
+            [f32::INFINITY, 0.0, f32::INFINITY]
+        );
+    }
+
+    #[test]
+    fn functions_of_several_operations_compute_what_they_do_in_32_bits() {
+        let values = "float x = 2.3, y = 0.7, t = 0.3; vec2 a = vec2(0.3, 0.8), b = vec2(-0.6, 0.2);
+            vec3 u = vec3(0.3, 0.5, -0.7), v = vec3(0.6, -0.2, 0.4); vec4 q = vec4(u, 0.4), r = vec4(v, -0.3);";
+        for expression in [
+            "vec3(mod(x, y), mod(a, b))",
+            "vec3(mod(q, r).wx, mod(v, y).z)",
+            "mix(u, v, t)",
+            "vec3(mix(x, y, t), mix(q, r, q).yw)",
+            "smoothstep(v, u, vec3(0.1))",
+            "vec3(smoothstep(0.1, y, t), smoothstep(0.1, 0.9, a))",
+            "vec3(dot(a, b), dot(u, v), dot(q, r))",
+            "vec3(length(a), length(u), length(q))",
+            "vec3(distance(a, b), distance(u, v), distance(q, r))",
+            "normalize(u) + vec3(normalize(a), normalize(q).w)",
+            "faceforward(u, v, u + v) + faceforward(v, u, -u)",
+            "reflect(u, v) + vec3(reflect(a, b), reflect(q, r).w)",
+            "refract(normalize(u), normalize(v), 0.8) + vec3(refract(normalize(a), normalize(b), y), 0.0)",
+            "cross(u, v)",
+        ] {
+            let [single, half] = colors(&format!("{values} c = vec4({expression}, 1.0);"));
+            for (single, half) in single.into_iter().zip(half) {
+                assert!((single - half).abs() < 4e-3, "{expression}: {single} {half}");
+            }
+            assert_ne!(single, half, "{expression}");
+        }
+        let total = format!("{values} c = vec4(refract(normalize(u), normalize(v.zxy), 3.0), 1.0);");
+        assert_eq!(emulated(&total), [0.0; 3]);
     }
 
     #[test]

@@ -28,8 +28,7 @@ pub(super) struct Unit {
     pub(super) at: Span,
 }
 
-/// The declarations whose values the emulation can round: of floats and vectors of floats, which are written
-/// as wholes or by components, outside of macros.
+/// The declarations whose values the emulation can round: of floats and vectors of floats, outside of macros.
 pub(super) fn units(checked: &Checked, text: &str) -> Vec<Unit> {
     let tree = &checked.tree;
     let refused = refused(tree);
@@ -112,39 +111,42 @@ pub(super) fn is_float(ty: Type) -> bool {
     matches!(ty, Type::Scalar(Scalar::Float) | Type::Vector(Scalar::Float, _))
 }
 
-/// Variables that are written in ways that the emulation does not follow: by a function, by `++`, by an
-/// index, or in the middle of an expression.
+/// Variables that are written in ways that the emulation does not follow: by a function, or by `+=` or `++`
+/// in the middle of an expression.
 fn refused(tree: &Tree) -> HashSet<VariableId> {
-    let statements = assignments(tree);
+    let statements = updates(tree);
     let mut refused = HashSet::new();
     for id in tree.exprs.ids() {
-        tree.each_write(id, |target, _| {
-            let is_assignment = statements.contains(&id) && matches!(tree[id].kind, ExprKind::Assign { .. });
-            let is_plain = matches!(
-                tree[target].kind,
-                ExprKind::Variable(_) | ExprKind::Swizzle { .. }
-            );
-            let is_outside = tree[id].at.is_expanded();
-            if let Some(variable) = tree.root_variable(target)
-                && (!is_assignment || !is_plain || is_outside)
-            {
-                refused.insert(variable);
+        tree.each_write(id, |target, value| {
+            if value.is_none() && !statements.contains(&id) {
+                refused.extend(tree.root_variable(target));
             }
         });
     }
     refused
 }
 
-/// The assignments that are statements, or steps of loops.
-fn assignments(tree: &Tree) -> HashSet<ExprId> {
-    let mut found = HashSet::new();
+/// The compound assignments and the steps that are statements, or in the third part of `for`.
+fn updates(tree: &Tree) -> HashSet<ExprId> {
+    let mut pending = Vec::new();
     for (_, function) in tree.functions.iter() {
-        if let Some(body) = &function.body {
-            walk::each(body, &mut |statement| match &statement.kind {
-                StatementKind::Expression(root) => found.extend([*root]),
-                StatementKind::For { step, .. } => found.extend(*step),
+        walk::each(
+            function.body.as_deref().unwrap_or_default(),
+            &mut |statement| match &statement.kind {
+                StatementKind::Expression(root) => pending.push(*root),
+                StatementKind::For { step, .. } => pending.extend(*step),
                 _ => {}
-            });
+            },
+        );
+    }
+    let mut found = HashSet::new();
+    while let Some(root) = pending.pop() {
+        match tree[root].kind {
+            ExprKind::Sequence { first, second } => pending.extend([first, second]),
+            ExprKind::Assign { .. } | ExprKind::Step { .. } => {
+                found.insert(root);
+            }
+            _ => {}
         }
     }
     found
@@ -155,10 +157,8 @@ fn assignments(tree: &Tree) -> HashSet<ExprId> {
 fn type_before(text: &str, name: Span) -> Option<Span> {
     let word_before = |end: usize| {
         let end = text[..end].trim_end().len();
-        let start = text[..end]
-            .rfind(|character: char| !character.is_ascii_alphanumeric() && character != '_')
-            .map_or(0, |at| at + 1);
-        (start, end)
+        let word = text[..end].trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_');
+        (word.len(), end)
     };
     let (start, end) = word_before(name.start as usize);
     let is_type = ["float", "vec2", "vec3", "vec4"].contains(&&text[start..end]);
@@ -179,7 +179,8 @@ mod tests {
 
     #[test]
     fn qualifiers_stand_in_front_of_types() {
-        let text = "float f(in vec3 p) { highp vec2 q = p.xy; float a = 1.0, b = 2.0; q.x += a; b++; return q.x + b; }
+        let text = "// é
+float f(in vec3 p) { highp vec2 q = p.xy; float a = 1.0, b = 2.0; q.x += a; a++; return q.x + b++; }
 void mainImage(out vec4 c, in vec2 p) { c = vec4(f(p.xyy)); }";
         let mut files = Files::default();
         let file = files.add(File::new("a.glsl", text));
@@ -188,13 +189,13 @@ void mainImage(out vec4 c, in vec2 p) { c = vec4(f(p.xyy)); }";
             .into_iter()
             .map(|unit| (unit.names.join(" "), unit.at.start, unit.at.end - unit.at.start))
             .collect();
-        // `b++` is not emulated, and one declaration has one precision.
+        // `b++` in an expression is not emulated, and one declaration has one precision.
         assert_eq!(
             found,
             [
-                ("f()".to_owned(), 0, 0),
-                ("p".to_owned(), 11, 0),
-                ("q".to_owned(), 21, 6)
+                ("f()".to_owned(), 6, 0),
+                ("p".to_owned(), 17, 0),
+                ("q".to_owned(), 27, 6)
             ]
         );
     }

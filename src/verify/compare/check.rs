@@ -182,6 +182,17 @@ pub fn precision(expected: &Image, actual: &Image, undefined: &[bool]) -> Vec<Pi
     undefined.iter().enumerate().map(status).collect()
 }
 
+/// The number of pixels of two images whose difference is visible: more than [`SEEN`].
+///
+/// # Panics
+/// If the sizes differ.
+#[must_use]
+pub fn visible_pixels(one: &Image, other: &Image) -> u64 {
+    let statuses = precision(one, other, &vec![false; one.pixels().len()]);
+    let visible = statuses.iter().filter(|status| **status == PixelStatus::Differs);
+    visible.count() as u64
+}
+
 /// The toolchain check: compares the bits of red, green and blue of the GPU's image in f32, `actual`, with
 /// the CPU's in f32, `expected`. All NaN are equal: GLSL gives their bits no meaning. So are the two zeros:
 /// Vulkan leaves the sign of zero to the driver unless `SignedZeroInfNanPreserve` requires it; llvmpipe 22.3

@@ -23,6 +23,7 @@ pub use algorithm::{
 pub(crate) use algorithm::{changed_by_rounding, count_tied, exclude_tied};
 pub use check::{
     CheckSummary, EXACT_TOLERANCE, PixelStatus, SEEN, Share, TOLERANCE, diff_levels, precision, toolchain,
+    visible_pixels,
 };
 pub use images::{Comparison, Pixel, compare, compare_within};
 pub use legend::{DiffLevel, IN_BITS, Legend, SEEN_BY_EYE, difference};
