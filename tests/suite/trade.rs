@@ -4,6 +4,7 @@
 use std::fs;
 
 use serde_json::Value;
+use toyproof::gpu::lavapipe_manifest;
 
 use crate::program::toyproof;
 use crate::requirements::require_driver;
@@ -382,7 +383,7 @@ void mainImage(out vec4 fragColor, in vec2 fragCoord) {
         &["trade", "a.glsl", "--mediump", "--size", "96x54", "-o", "out"],
     );
     assert_eq!(run.code, 0, "{}", run.stderr);
-    if require_driver() {
+    if require_driver() && lavapipe_manifest().is_some() {
         let line = "lavapipe in 16 bits: 0 visible pixels, 0 unlike the emulation; ";
         assert!(run.stdout.contains(line), "{}", run.stdout);
     }

@@ -124,16 +124,21 @@ impl<'a> Emulation<'a> {
                 ExprKind::Binary { .. } | ExprKind::BuiltIn { .. } | ExprKind::Unary { .. }
             );
             let is_update = matches!(kind, ExprKind::Assign { op: Some(_), .. } | ExprKind::Step { .. });
-            if (is_operation || is_update) && is_float(tree[id].ty) && precision == Precision::Medium {
-                self.operations.insert(id);
+            if is_float(tree[id].ty) && precision == Precision::Medium {
+                if is_operation || is_update {
+                    self.operations.insert(id);
+                }
                 if is_operation {
                     self.round(id);
                 }
-                kind.for_each_operand(|operand| {
-                    if precisions.get(&operand) == Some(&Precision::Any) {
-                        self.round(operand);
-                    }
-                });
+                // Parameters determine the precision of arguments.
+                if !matches!(kind, ExprKind::Call { .. }) {
+                    kind.for_each_operand(|operand| {
+                        if precisions.get(&operand) == Some(&Precision::Any) {
+                            self.round(operand);
+                        }
+                    });
+                }
             }
             precisions.insert(id, precision);
         }

@@ -32,10 +32,10 @@ float sum(vec4 x) { return H(sum(x.xyz) + x.w); }
 COMMON(float, float) COMMON(vec2, vec2) COMMON(vec3, vec3) COMMON(vec4, vec4)
 COMMON(vec2, float) COMMON(vec3, float) COMMON(vec4, float)
 
-#define SMOOTH(T, S) \\
+#define SMOOTH(T) \\
     T cubic(T t) { return H(H(t * t) * H(3.0 - H(2.0 * t))); } \\
     T h_smoothstep(T low, T high, T x) { return cubic(clamp(H(H(x - low) / H(high - low)), 0.0, 1.0)); }
-SMOOTH(float, float) SMOOTH(vec2, vec2) SMOOTH(vec3, vec3) SMOOTH(vec4, vec4)
+SMOOTH(float) SMOOTH(vec2) SMOOTH(vec3) SMOOTH(vec4)
 #define SMOOTH_BETWEEN(T) \\
     T h_smoothstep(float low, float high, T x) { return h_smoothstep(T(low), T(high), x); }
 SMOOTH_BETWEEN(vec2) SMOOTH_BETWEEN(vec3) SMOOTH_BETWEEN(vec4)

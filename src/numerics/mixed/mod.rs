@@ -236,9 +236,23 @@ mod tests {
     }
 
     #[test]
+    fn constants_have_the_precision_of_what_they_are_combined_with() {
+        // The number of 16 bits next to 0.1, times 3, is halfway between 1228/4096 and 1229/4096; 0.3 is
+        // nearer to the latter.
+        let values = "float x = 3.0; vec2 v = vec2(x, 0.1); v.x += 0.0;";
+        assert_eq!(
+            emulated(&format!(
+                "{values} c = vec4(vec2(x, 0.1) * x, (x > 5.0 ? x : 0.1) * x, 1.0);"
+            )),
+            [9.0, 1228.0 / 4096.0, 1228.0 / 4096.0]
+        );
+    }
+
+    #[test]
     fn functions_of_several_operations_compute_what_they_do_in_32_bits() {
         let values = "float x = 2.3, y = 0.7, t = 0.3; vec2 a = vec2(0.3, 0.8), b = vec2(-0.6, 0.2);
-            vec3 u = vec3(0.3, 0.5, -0.7), v = vec3(0.6, -0.2, 0.4); vec4 q = vec4(u, 0.4), r = vec4(v, -0.3);";
+            vec3 u = vec3(0.3, 0.5, -0.7), v = vec3(0.6, -0.2, 0.4);
+            vec4 q = vec4(u, 0.4), r = vec4(v, -0.3);";
         for expression in [
             "vec3(mod(x, y), mod(a, b))",
             "vec3(mod(q, r).wx, mod(v, y).z)",

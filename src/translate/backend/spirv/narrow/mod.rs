@@ -1,8 +1,8 @@
 //! Narrows to floats of 16 bits what a shader rounds to 16 bits, for drivers that have them.
 //!
 //! The shader calls [`ROUNDING_FUNCTION`] wherever a value has 16 bits. Here a value is *exact* if it always
-//! is a number of 16 bits: the result of such a call, some constants, what is loaded from a variable that gets
-//! nothing else, and what is put together from such values. An exact value gets a twin of 16 bits, exact
+//! is a number of 16 bits: the result of such a call, some constants, what is loaded from a variable that
+//! gets nothing else, and what is composed of such values. An exact value gets a copy of 16 bits, exact
 //! variables store 16 bits, and an operation of exact values whose result is rounded is one of 16 bits.
 //! Drivers remove the values that nothing uses any more.
 
@@ -30,7 +30,7 @@ pub fn narrowed(words: &[u32]) -> Vec<u32> {
     let mut narrowing = Narrowing {
         module,
         bound: words[BOUND],
-        twins: HashMap::new(),
+        halves: HashMap::new(),
         declarations: Vec::new(),
         types: HashMap::new(),
         pointers: HashMap::new(),
@@ -40,19 +40,19 @@ pub fn narrowed(words: &[u32]) -> Vec<u32> {
     narrowing.rewrite(words)
 }
 
-/// A module in which exact values get twins of 16 bits.
+/// A module in which exact values get copies of 16 bits.
 struct Narrowing<'a> {
     module: Module<'a>,
     bound: u32,
-    /// The twins of values.
-    twins: HashMap<u32, u32>,
+    /// The copies of values.
+    halves: HashMap<u32, u32>,
     /// The types and constants of 16 bits.
     declarations: Vec<u32>,
     /// The types of 16 bits by their numbers of components.
     types: HashMap<u32, u32>,
     /// The types of pointers to these, by storage class and number of components.
     pointers: HashMap<(u32, u32), u32>,
-    /// Parameters whose twins follow the variables of the function.
+    /// Parameters whose copies follow the variables of the function.
     parameters: Vec<u32>,
 }
 
@@ -62,16 +62,16 @@ impl Narrowing<'_> {
         self.bound - 1
     }
 
-    fn twin(&mut self, value: u32) -> u32 {
-        if let Some(&twin) = self.twins.get(&value) {
-            return twin;
+    fn half(&mut self, value: u32) -> u32 {
+        if let Some(&half) = self.halves.get(&value) {
+            return half;
         }
-        let twin = self.fresh();
-        self.twins.insert(value, twin);
-        twin
+        let half = self.fresh();
+        self.halves.insert(value, half);
+        half
     }
 
-    /// Declares the types, and the twins of constants.
+    /// Declares the types, and the copies of constants.
     fn declare(&mut self, words: &[u32]) {
         for size in 1..=4 {
             let id = self.fresh();
@@ -95,12 +95,12 @@ impl Narrowing<'_> {
                 Some(Op::Function) => break,
                 Some(Op::Constant) if self.module.is_exact(instruction[2]) => {
                     let bits = f16::from_f32(f32::from_bits(instruction[3])).to_bits();
-                    let operands = [self.types[&1], self.twin(instruction[2]), u32::from(bits)];
+                    let operands = [self.types[&1], self.half(instruction[2]), u32::from(bits)];
                     push(&mut self.declarations, Op::Constant, &operands);
                 }
                 Some(Op::ConstantComposite | Op::ConstantNull) => {
-                    let twin = self.twin_instruction(instruction);
-                    self.declarations.extend(twin);
+                    let half = self.half_instruction(instruction);
+                    self.declarations.extend(half);
                 }
                 _ => {}
             }
@@ -108,29 +108,29 @@ impl Narrowing<'_> {
     }
 
     /// An instruction of 16 bits in place of one whose operands and result are exact; empty if it has none.
-    fn twin_instruction(&mut self, instruction: &[u32]) -> Vec<u32> {
+    fn half_instruction(&mut self, instruction: &[u32]) -> Vec<u32> {
         let kept = self
             .module
             .kept(instruction)
             .filter(|_| self.module.is_exact(instruction[2]));
         match kept {
-            Some(operands) => self.of_twins(instruction, &operands, instruction[2]),
+            Some(operands) => self.of_halves(instruction, &operands, instruction[2]),
             None => Vec::new(),
         }
     }
 
-    /// An instruction of the twins of its operands, which computes the twin of a value.
-    fn of_twins(&mut self, instruction: &[u32], operands: &[usize], value: u32) -> Vec<u32> {
-        let mut twin = instruction.to_vec();
-        twin[1] = self.narrow_type(value);
-        twin[2] = self.twin(value);
+    /// An instruction of the copies of its operands, which computes the copy of a value.
+    fn of_halves(&mut self, instruction: &[u32], operands: &[usize], value: u32) -> Vec<u32> {
+        let mut half = instruction.to_vec();
+        half[1] = self.narrow_type(value);
+        half[2] = self.half(value);
         for &at in operands {
-            twin[at] = self.twin(twin[at]);
+            half[at] = self.half(half[at]);
         }
-        twin
+        half
     }
 
-    /// The type of the twin of a value.
+    /// The type of the copy of a value.
     fn narrow_type(&self, value: u32) -> u32 {
         let size = self.module.floats(value).map_or(1, |(_, size)| size);
         self.types[&size]
@@ -150,7 +150,7 @@ impl Narrowing<'_> {
             let precedes_code = matches!(op, Op::FunctionParameter | Op::Label | Op::Variable | Op::Line);
             if !precedes_code {
                 for parameter in std::mem::take(&mut self.parameters) {
-                    self.convert_to_twin(&mut code, parameter);
+                    self.convert_to_half(&mut code, parameter);
                 }
             }
             self.rewrite_instruction(&mut code, op, instruction);
@@ -172,37 +172,37 @@ impl Narrowing<'_> {
                     narrow[1] = self.pointers[&pointee];
                 }
                 if let (Op::Variable, Some(initializer)) = (op, narrow.get(4).copied()) {
-                    narrow[4] = self.twin(initializer);
+                    narrow[4] = self.half(initializer);
                 }
                 code.extend(narrow);
             }
             Op::Store if is_exact(self, 1) => {
-                let value = self.twin(instruction[2]);
+                let value = self.half(instruction[2]);
                 push(code, op, &[instruction[1], value]);
             }
             Op::Load if is_exact(self, 2) => {
                 let narrow = [
                     self.narrow_type(instruction[2]),
-                    self.twin(instruction[2]),
+                    self.half(instruction[2]),
                     instruction[3],
                 ];
                 push(code, op, &narrow);
-                self.convert_from_twin(code, instruction);
+                self.convert_from_half(code, instruction);
             }
             Op::FunctionCall if self.module.is_rounding(instruction[3]) => {
                 let [value, argument] = [instruction[2], instruction[4]];
                 if let Some((operation, operands)) = self.module.narrow_operation(argument) {
-                    let narrow = self.of_twins(operation, &operands, value);
+                    let narrow = self.of_halves(operation, &operands, value);
                     code.extend(narrow);
                 } else {
-                    let narrow = [self.narrow_type(value), self.twin(value), argument];
+                    let narrow = [self.narrow_type(value), self.half(value), argument];
                     push(code, Op::FConvert, &narrow);
                 }
-                self.convert_from_twin(code, instruction);
+                self.convert_from_half(code, instruction);
             }
             Op::FunctionCall if is_exact(self, 2) => {
                 code.extend(instruction);
-                self.convert_to_twin(code, instruction[2]);
+                self.convert_to_half(code, instruction[2]);
             }
             Op::FunctionParameter => {
                 code.extend(instruction);
@@ -213,21 +213,21 @@ impl Narrowing<'_> {
             Op::ConstantComposite | Op::ConstantNull => code.extend(instruction),
             _ => {
                 code.extend(instruction);
-                let twin = self.twin_instruction(instruction);
-                code.extend(twin);
+                let half = self.half_instruction(instruction);
+                code.extend(half);
             }
         }
     }
 
     /// Appends the conversion of a value to 16 bits, which changes nothing.
-    fn convert_to_twin(&mut self, code: &mut Vec<u32>, value: u32) {
-        let operands = [self.narrow_type(value), self.twin(value), value];
+    fn convert_to_half(&mut self, code: &mut Vec<u32>, value: u32) {
+        let operands = [self.narrow_type(value), self.half(value), value];
         push(code, Op::FConvert, &operands);
     }
 
-    /// Appends the conversion of the twin to the value of an instruction.
-    fn convert_from_twin(&mut self, code: &mut Vec<u32>, instruction: &[u32]) {
-        let twin = self.twin(instruction[2]);
-        push(code, Op::FConvert, &[instruction[1], instruction[2], twin]);
+    /// Appends the conversion of the copy to the value of an instruction.
+    fn convert_from_half(&mut self, code: &mut Vec<u32>, instruction: &[u32]) {
+        let half = self.half(instruction[2]);
+        push(code, Op::FConvert, &[instruction[1], instruction[2], half]);
     }
 }
